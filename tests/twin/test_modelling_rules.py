@@ -147,7 +147,7 @@ async def served() -> Seen:
         missing = await not_loaded(server)
         listed = server.space.node("MachineTool.Production.ProductionPlan.Job1.ProductionPrograms")
         names = [name for name in await children(listed) if name != "NodeVersion"]
-        keys = ("program.feed", "block.line", "state.program")
+        keys = ("program.feed", "block.texts", "block.line", "state.program")
         historized = sum(len(target.histories) for key in keys for target in publisher._targets[key])
         await server.start()
         answers = [await answer(begun, listening) for begun in (b"", b"HELF\x40\x00\x00\x00half")]
@@ -217,7 +217,7 @@ def test_all_that_types_ask_for_is_there_and_nothing_stands_for_others(seen: See
     assert seen.found == []
     assert seen.asked > 300
     assert seen.programs == [HUB_ROUGH.name]
-    assert seen.historized == 3
+    assert seen.historized == 4
 
 
 def test_the_server_has_all_rules_of_the_nodesets(seen: Seen) -> None:

@@ -160,3 +160,36 @@ def test_stamps_are_those_of_the_wall(program: TwinProgram) -> None:
     asyncio.run(run_with(program, [agent], Agent(program)))
     for values in agent.values.values():
         assert all(begun - timedelta(hours=1) < time < begun + timedelta(hours=1) for time, _ in values)
+
+
+def test_times_are_in_order_when_the_program_is_held_and_goes_on(program: TwinProgram) -> None:
+    """Held while axes move, slowed down, and reset, by a wall clock that an agent looks at as well."""
+    lines: list[str] = []
+
+    async def operate(speed: float | None) -> None:
+        with socket.create_server(("127.0.0.1", 0)) as listening:
+            adapter = MTConnectAdapter(program, listening)
+            adapter._send = lines.append  # type: ignore[method-assign, assignment]
+            twin = Twin(program, Playback(program.timed, speed=speed, loop=True), 0.005)
+            twin.outlets.append(adapter)
+            running = asyncio.create_task(twin.run())
+            for k in range(12):
+                await asyncio.sleep(0.02)
+                if await twin.hold():
+                    await asyncio.sleep(0.01 * (k % 2))
+                    await twin.start()
+                await twin.set_override(100.0 - k)
+            await twin.hold()
+            await twin.reset()
+            running.cancel()
+            await asyncio.gather(running, return_exceptions=True)
+
+    for speed in (1.0, 50.0, None):
+        lines.clear()
+        asyncio.run(operate(speed))
+        agent = Agent(program)
+        for line in lines:
+            agent.take(line.rstrip("\n"))  # asserts that no time is before the last one
+        states = [value for _, value in agent.values["exec"]]
+        assert states.count("FEED_HOLD") >= 10
+        assert states.count("ACTIVE") >= 10

@@ -86,6 +86,8 @@ def each_line_is_shown_with_the_ones_around_it(seen: dict[str, Any]) -> None:
     shown = {tuple(texts) for _, texts in seen["blocks"]}
     moving = {int(run.line[row]) for row in range(5, len(run))}
     assert {tuple(lines[line - 2 : line + 1]) for line in moving} <= shown
+    ran = seen["ran"]
+    assert ran == [told for told in sorted(seen["blocks"])[1:] if told[0] <= ran[-1][0]]
     assert "METHOD" in seen["messages"]
     assert max(speed for _, speed in seen["speeds"]) == 2500.0
 

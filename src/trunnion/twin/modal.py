@@ -70,7 +70,7 @@ class Blocks:
     def __init__(self, timed: TimedRun, texts: Sequence[str]) -> None:
         run = timed.run
         self._run, self._timed = run, timed
-        self._lines = [[line.rstrip("\r") for line in text.split("\n")] for text in texts]
+        self._lines = [[line.strip() for line in text.split("\n")] for text in texts]
         self._names = [PurePath(file).name for file in run.files]
         events = [each.event for each in timed.events]
         self._gap = np.array([min(event.before_row, len(run)) for event in events], np.int64)
@@ -166,7 +166,7 @@ class Blocks:
 
     def _texts(self, file: int, line: int) -> tuple[str, str, str]:
         lines = self._lines[file] if file < len(self._lines) else []
-        before, this, after = (lines[k].strip() if 0 <= k < len(lines) else "" for k in (line - 2, line - 1, line))
+        before, this, after = (lines[k] if 0 <= k < len(lines) else "" for k in (line - 2, line - 1, line))
         return before, this, after
 
     def _g_functions(self, row: int) -> tuple[int, ...]:

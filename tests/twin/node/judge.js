@@ -179,6 +179,9 @@ async function main() {
     seen.axes[name].values = numbersInOrder(items[name]);
     seen.positions[name].sort(([one], [other]) => one - other);
   }
+  const blockNode = await child(session, channel.nodeId, "ActProgramBlock");
+  const ran = await session.readHistoryValue({ nodeId: blockNode }, new Date(started - 1000), new Date(Date.now() + 1000));
+  seen.ran = ran.historyData.dataValues.map((value) => [microseconds(value), value.value.value]);
   step("reset");
   seen.calls.reset = await call("Reset");
   seen.afterReset = await read(session, timeNode);

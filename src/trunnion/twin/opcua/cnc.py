@@ -137,6 +137,7 @@ async def _channel(space: Space, program: TwinProgram) -> None:
     space.show("block.number", _STRING, f"{path}.ActProgramLine")
     space.show("block.line", _UINT32, f"{path}.ActProgramFileOffset")
     await space.historize("program.feed", f"{path}.ActFeedrate")
+    await space.historize("block.texts", f"{path}.ActProgramBlock", _STRING)
     await space.historize("block.line", f"{path}.ActProgramFileOffset", _UINT32)
     await space.historize("state.program", f"{path}.ActProgramStatus", _INT32)
     for name in ("ActFeedrate", "CmdFeedrate"):

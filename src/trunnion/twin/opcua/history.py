@@ -6,36 +6,51 @@ from typing import Any, Final
 import numpy as np
 from asyncua import ua
 from asyncua.server.history import HistoryStorageInterface
+from numpy.typing import NDArray
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Ints
 from trunnion.twin.opcua.values import PublishedValue, published
 
 #: Values that are kept of a node, and values in one answer.
 KEPT: Final = 100_000
 _MOST_IN_ANSWER: Final = 10_000
 
+#: Characters of texts in one answer: with all of them Chinese it is still one message.
+_MOST_CHARACTERS: Final = 1_000_000
+
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 
+#: What values of a type are kept as; of others they are kept as they are.
+_KEPT_AS: Final = {ua.VariantType.Double: np.float64, ua.VariantType.Int32: np.int64, ua.VariantType.UInt32: np.int64}
 
-class NumberHistory:
-    """The last values of a number; older ones are forgotten. Times are microseconds since 1970, ascending."""
+
+class ValueHistory:
+    """The last values of a node; older ones are forgotten. Times are microseconds since 1970, ascending."""
 
     def __init__(self, kept: int = KEPT, kind: ua.VariantType = ua.VariantType.Double) -> None:
         self._kind = kind
-        self._times, self._values = np.zeros(kept, np.int64), np.zeros(kept)
+        self._times, self._values = np.zeros(kept, np.int64), np.zeros(kept, _KEPT_AS.get(kind, np.object_))
         self._kept, self._count = kept, 0
 
-    def add(self, time: int, value: float) -> None:
-        """Keep a value, which is later than all others."""
+    def add(self, time: int, value: Any) -> None:
+        """Keep a value, which is later than all others, and which nobody changes any more."""
         place = self._count % self._kept
         self._times[place], self._values[place] = time, value
         self._count += 1
 
-    def told(self, value: float, moment: datetime) -> PublishedValue:
+    def told(self, value: Any, moment: datetime) -> PublishedValue:
         """Return a value of it as clients get it: of its own type."""
-        return published(value if self._kind is ua.VariantType.Double else int(value), self._kind, moment)
+        return published(value, self._kind, moment)
 
-    def between(self, first: int, last: int) -> tuple[Ints, Floats]:
+    def in_one_answer(self, values: NDArray[Any]) -> int:
+        """How many of some values of it go into one answer, from the first on."""
+        most = values[:_MOST_IN_ANSWER]
+        if most.dtype != np.object_:
+            return len(most)
+        sizes = np.cumsum([sum(map(len, texts)) for texts in most.tolist()])
+        return max(int(np.searchsorted(sizes, _MOST_CHARACTERS, "right")), 1)
+
+    def between(self, first: int, last: int) -> tuple[Ints, NDArray[Any]]:
         """Return times and values from ``first`` to ``last``, both of them included, in order."""
         if self._count <= self._kept:
             times, values = self._times[: self._count], self._values[: self._count]
@@ -51,7 +66,7 @@ class TwinHistory(HistoryStorageInterface):
 
     def __init__(self) -> None:
         super().__init__(_MOST_IN_ANSWER)
-        self.numbers: dict[ua.NodeId, NumberHistory] = {}
+        self.of_node: dict[ua.NodeId, ValueHistory] = {}
 
     async def init(self) -> None:
         """Nothing is to be opened."""
@@ -66,7 +81,7 @@ class TwinHistory(HistoryStorageInterface):
 
         The second result is the time at which the next answer goes on; None: these are all.
         """
-        history = self.numbers.get(node_id)
+        history = self.of_node.get(node_id)
         if history is None:
             raise ua.uaerrors.BadHistoryOperationUnsupported
         first, last = _microseconds(start), _microseconds(end)
@@ -75,7 +90,7 @@ class TwinHistory(HistoryStorageInterface):
         times, values = history.between(low, high)
         if backwards:
             times, values = times[::-1], values[::-1]
-        most = min(nb_values, _MOST_IN_ANSWER) if nb_values > 0 else _MOST_IN_ANSWER
+        most = history.in_one_answer(values[:nb_values] if nb_values > 0 else values)
         more = _moment(int(times[most])) if len(times) > most and most != nb_values else None
         found = zip(times[:most].tolist(), values[:most].tolist(), strict=True)
         return [history.told(value, _moment(time)) for time, value in found], more

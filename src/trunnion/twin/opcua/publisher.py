@@ -9,7 +9,7 @@ from asyncua.server.address_space import AttributeValue
 
 from trunnion.records import dataclass
 from trunnion.twin.opcua.columns import Columns
-from trunnion.twin.opcua.history import NumberHistory, TwinHistory
+from trunnion.twin.opcua.history import TwinHistory, ValueHistory
 from trunnion.twin.opcua.space import Space
 from trunnion.twin.opcua.values import PublishedValue, published
 
@@ -27,7 +27,7 @@ class _Target:
 
     kind: ua.VariantType
     variables: list[AttributeValue]
-    histories: list[NumberHistory]
+    histories: list[ValueHistory]
     last: Any = _NOTHING
 
     def is_watched(self) -> bool:
@@ -54,7 +54,7 @@ class Publisher:
         self._targets: dict[str, list[_Target]] = {}
         for (key, kind), shown in space.shown.items():
             variables = [nodes[node].attributes[ua.AttributeIds.Value] for node in shown.nodes]
-            histories = [history.numbers.setdefault(node, NumberHistory(kind=kind)) for node in shown.historized]
+            histories = [history.of_node.setdefault(node, ValueHistory(kind=kind)) for node in shown.historized]
             self._targets.setdefault(key, []).append(_Target(kind, variables, histories))
 
     async def show(self, columns: Columns, stamps: Sequence[datetime], microseconds: Sequence[int]) -> None:

@@ -183,7 +183,7 @@ class Space:
         self.shown.setdefault((key, kind), Shown()).nodes += nodes
 
     async def historize(self, key: str, path: str, kind: ua.VariantType = ua.VariantType.Double) -> None:
-        """Keep the history of a number for clients that read it from a variable."""
+        """Keep the history of a value for clients that read it from a variable."""
         access = ua.DataValue(ua.Variant(_READ | _HISTORY, ua.VariantType.Byte))
         for attribute in (ua.AttributeIds.AccessLevel, ua.AttributeIds.UserAccessLevel):
             await self.node(path).write_attribute(attribute, access)
