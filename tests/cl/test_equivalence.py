@@ -1,6 +1,7 @@
 """One path, written in every dialect, becomes the same toolpath; and so it does in every dialect that we write."""
 
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -29,8 +30,16 @@ def test_a_path_is_the_same_in_every_dialect(tmp_path: Path, steps: list[Step], 
         toolpath = read_cl(path, ClReading(strict=True))
         assert toolpath.dialect == dialect
         found[dialect] = content(toolpath)
+        offsets = [operation.work_offset for operation in toolpath.operations]
+        assert all(offsets) == any(offsets) == (dialect == "trunnion")
+        numbered = enumerate(toolpath.operations, 1)
+        toolpath = replace(toolpath, operations=tuple(replace(one, work_offset=number) for number, one in numbered))
         for ours in OURS:
-            found[f"{dialect} as {ours}"] = content(rewritten(toolpath, ours, inch, tmp_path / "again"))
+            again = rewritten(toolpath, ours, inch, tmp_path / "again")
+            found[f"{dialect} as {ours}"] = content(again)
+            stated = [operation.work_offset for operation in again.operations]
+            assert any(stated) == (ours == "trunnion")
+            assert ours != "trunnion" or stated == list(range(1, len(offsets) + 1))
     expected = found.pop("clsf")
     assert len(found) >= 3
     for dialect, other in found.items():

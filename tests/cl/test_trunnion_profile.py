@@ -17,7 +17,8 @@ from trunnion.model.toolpath import Frame, LoadTool, Tool
 HEAD = "$$-> TRUNNION / 1\nUNITS/MM\n$$-> STOCK / BOX,60,50,40,-30,-25,-40\n"
 BEGIN = "TOOL PATH/FINISH,TOOL,BALL 10\n"
 TOOL = "$$-> TOOL / MILL,CORNER,5,DIAMETER,10,LENGTH,60,FLUTE,25,EXTENSION,42,GAUGE,121.5\n$$-> HOLDER / HSK 63/ER32\n"
-BODY = "MSYS/1,2,3,0,1,0,0,0,1\nLOADTL/7,ADJUST,9\nSELCTL/8\nFEDRAT/MMPM,500\nRAPID\nGOTO/0,0,9,0.6,0,0.8\nGOTO/0,0,0\n"
+BODY = "MSYS/1,2,3,0,1,0,0,0,1\n$$-> WORK-OFFSET / 2\n"
+BODY += "LOADTL/7,ADJUST,9\nSELCTL/8\nFEDRAT/MMPM,500\nRAPID\nGOTO/0,0,9,0.6,0,0.8\nGOTO/0,0,0\n"
 END = "END-OF-PATH\nFINI\n"
 WHOLE = HEAD + BEGIN + TOOL + BODY + END
 
@@ -30,6 +31,7 @@ def test_the_whole_tool_plane_and_stock_are_read(read: Read) -> None:
         kind="MILL", name="BALL 10", diameter=10.0, corner_radius=5.0, length=60.0, flute_length=25.0, extension=42.0,
         set_length=121.5, holder="HSK 63/ER32",
     )  # fmt: skip
+    assert operation.work_offset == 2
     assert operation.frame == Frame((1.0, 2.0, 3.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     assert next(event.adjust for event in operation.events if isinstance(event, LoadTool)) == 9
 
@@ -59,6 +61,7 @@ def test_what_is_written_is_what_was_read(inch: bool, read: Read) -> None:
         for field in Tool.__dataclass_fields__:
             value, again = getattr(one.tool, field), getattr(other.tool, field)
             assert again == (value if isinstance(value, str | None) else pytest.approx(value)), field
+        assert other.work_offset == one.work_offset == 2
         np.testing.assert_allclose(other.frame.origin, one.frame.origin, atol=1e-7)
         assert (other.frame.x, other.frame.y) == (one.frame.x, one.frame.y)
         np.testing.assert_allclose(other.moves.tip, one.moves.tip, atol=1e-9)
@@ -97,14 +100,22 @@ def test_the_first_line_settles_the_dialect_and_only_there() -> None:
         ("LENGTH,60", "CORNER,60", 5, "TOOL has CORNER twice"),
         ("HOLDER", "HOLDR", 6, "HOLDR"),
         ("$$-> HOLDER", "$$ -> HOLDER", 6, "a comment begins with -> HOLDER"),
-        ("SELCTL/8", "CLAMP/ON", 9, "CLAMP"),
-        ("SELCTL/8", "LOAD/TOOL,8", 9, "LOAD"),
-        ("SELCTL/8", "SEQNO/ON", 9, "SEQNO"),
-        ("SELCTL/8", "COOLNT/FLOD", 9, "FLOD"),
-        ("SELCTL/8", "PAINT/PATH", 9, "PAINT/PATH is not known"),
-        ("SELCTL/8", "GODLTA/1,2,3", 9, "GODLTA"),
-        ("SELCTL/8", "NURBS/", 9, "NURBS"),
-        ("FINI\n", "", 14, "FINI"),
+        ("OFFSET / 2", "OFFSET / 0", 8, "WORK-OFFSET / 0 is not known"),
+        ("OFFSET / 2", "OFFSET / 2.5", 8, "WORK-OFFSET"),
+        ("OFFSET / 2", "OFFSET / G55", 8, "WORK-OFFSET"),
+        ("OFFSET / 2", "OFFSET / 2,3", 8, "WORK-OFFSET"),
+        ("OFFSET / 2", "OFFSET / 2\n$$-> WORK-OFFSET / 3", 9, "work offset"),
+        (BEGIN, "$$-> WORK-OFFSET / 2\n" + BEGIN, 4, "WORK-OFFSET outside any operation"),
+        ("RAPID\nGOTO/0,0,9,0.6,0,0.8\n", "GOTO/0,0,9\n$$-> WORK-OFFSET / 2\n", 13, "WORK-OFFSET behind motion"),
+        (END, "END-OF-PATH\nTOOL PATH/B,TOOL,C\nFEDRAT/MMPM,9\nGOTO/0,0,9\n" + END, 16, "B states no work offset"),
+        ("SELCTL/8", "CLAMP/ON", 10, "CLAMP"),
+        ("SELCTL/8", "LOAD/TOOL,8", 10, "LOAD"),
+        ("SELCTL/8", "SEQNO/ON", 10, "SEQNO"),
+        ("SELCTL/8", "COOLNT/FLOD", 10, "FLOD"),
+        ("SELCTL/8", "PAINT/PATH", 10, "PAINT/PATH is not known"),
+        ("SELCTL/8", "GODLTA/1,2,3", 10, "GODLTA"),
+        ("SELCTL/8", "NURBS/", 10, "NURBS"),
+        ("FINI\n", "", 15, "FINI"),
         ("END-OF-PATH\nFINI\n", "", 4, "END-OF-PATH"),
     ],
 )

@@ -124,10 +124,10 @@ def test_inactive_operations_and_fixtures(tmp_path: Path) -> None:
         Thing(Label=name, Path=Thing(Commands=[command(name), command("G0", Z=99.0)])) for name in ("G54", "G55")
     ]
     objects = [fixtures[0], operation(*cut), operation(*cut, label="NO", Active=False), fixtures[1], operation(*cut)]
-    assert [each.name for each in read(tmp_path, *objects).operations] == ["POCKET", "POCKET G55"]
-    writer = trunnion_post.Writer()
-    writer.job(objects)
-    assert writer.offset_setting() == "G54,POCKET G55:G55"
+    found = read(tmp_path, *objects).operations
+    assert [(each.name, each.work_offset) for each in found] == [("POCKET", 1), ("POCKET G55", 2)]
+    fixtures[1].Path.Commands[0].Name = "G59.3"
+    assert read(tmp_path, *objects).operations[1].work_offset == 9
 
 
 def test_dressups_upon_each_other_are_the_operation_that_they_change(tmp_path: Path) -> None:

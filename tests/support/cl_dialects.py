@@ -173,7 +173,8 @@ class _Trunnion(_Clsf):
         ends = _Clsf.foot(self)
         self._open = True
         data = f"$$-> TOOL / MILL, LENGTH, 50, DIAMETER, {diameter:.6f}, CORNER, {corner:.6f}"
-        return [*ends, f"TOOL PATH/OP{number},TOOL,T{number}", data, f"LOADTL/{number}"]
+        offset = "$$-> WORK-OFFSET / 1"
+        return [*ends, f"TOOL PATH/OP{number},TOOL,T{number}", data, offset, f"LOADTL/{number}"]
 
 
 class _Ncl(_Writer):

@@ -92,6 +92,7 @@ def assemble_operation(
         file=diagnostics.file,
         splines=Splines.of(builder.curves),
         joined=tuple(builder.joined),
+        work_offset=builder.work_offset,
     )
     return turned(operation, builder.planes)
 

@@ -179,6 +179,7 @@ class OperationBuilder:
     points     what the file says of its points
     open_cycle  the cycle that is still on where it begins; None: there is none
     planes     planes in whose coordinates the points are; none: they are in those of the file
+    work_offset  which one of the control, from 1; 0: none is stated
     """
 
     name: str
@@ -207,3 +208,4 @@ class OperationBuilder:
     points: StatedPoints | None = None
     open_cycle: CycleOn | None = None
     planes: list[PlaneStatement] = field(default_factory=list)
+    work_offset: int = 0

@@ -113,6 +113,7 @@ class _Rows(NamedTuple):
             "normal of an arc": np.concatenate([a.normal for a in arcs]),
             "radius": np.concatenate([a.radius for a in arcs]),
             "number of turns": np.concatenate([a.full_turns for a in arcs]),
+            "work offset": np.concatenate([np.full(len(o.moves), o.work_offset) for o in operations]),
             "tool diameter": np.concatenate([np.full(len(o.moves), o.tool.diameter) for o in operations]),
         }
         line = np.concatenate([m.line for m in moves])

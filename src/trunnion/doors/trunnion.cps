@@ -33,17 +33,6 @@ allowSpiralMoves = false;
 allowedCircularPlanes = undefined; // any plane
 
 properties = {
-  workOffsets: {
-    title: "Several work offsets",
-    description: "CL data have no work offsets. Refused, or stated when posting: trunnion post --set work_offset=G54,NAME:G55.",
-    type: "enum",
-    values: [
-      {title: "refuse", id: "refuse"},
-      {title: "stated when posting", id: "stated"}
-    ],
-    value: "refuse",
-    scope: "post"
-  },
   probing: {
     title: "Probing",
     description: "Refused, or PROBE statements, for which the definition of the machine says what they become.",
@@ -203,13 +192,14 @@ function offsetOf(section) {
   return (section.workOffset > 0) ? section.workOffset : 1; // 0: the first
 }
 
-/** Several set-ups: each work offset is one zero, and several of them must be wanted. */
+/** Several set-ups: each work offset is one zero. Whether there are several, and whether any is stated. */
 function checkOffsets() {
   var first = {};
   var count = 0;
   for (var i = 0; i < getNumberOfSections(); ++i) {
     var section = getSection(i);
     var offset = offsetOf(section);
+    statesOffsets = statesOffsets || (section.workOffset > 0);
     if (!first.hasOwnProperty(offset)) {
       first[offset] = {section: section, name: nameOf(section, i)};
       count += 1;
@@ -224,18 +214,15 @@ function checkOffsets() {
       }
     }
   }
-  if (count > 1 && getProperty("workOffsets") != "stated") {
-    error("the program has " + count + " work offsets, which CL data cannot say: post each set-up by itself, or set the post property " +
-      "'Several work offsets' and state them when posting (trunnion post --set work_offset=...)");
-    return false;
-  }
   return count > 1;
 }
 
 var hasOffsets = false;
+var statesOffsets = false;
 
 function onOpen() {
   readInserts(getProperty("inserts"));
+  statesOffsets = false;
   hasOffsets = checkOffsets();
   writeln("$$-> TRUNNION / " + VERSION);
   if (programName) {
@@ -436,9 +423,8 @@ function onSection() {
   writeTool(tool);
   writePlane();
   writeTolerance();
-  if (hasOffsets) {
-    writeln("$$ WORK OFFSET " + offsetOf(currentSection));
-    writeln("PPRINT/WORK OFFSET " + offsetOf(currentSection));
+  if (statesOffsets) {
+    writeln("$$-> WORK-OFFSET / " + offsetOf(currentSection));
   }
   sayPending();
   if (tool.manualToolChange) {

@@ -39,8 +39,9 @@ _PLANES = {"G17": (0.0, 0.0, 1.0), "G18": (0.0, 1.0, 0.0), "G19": (1.0, 0.0, 0.0
 #: The plane of an operation without a work plane.
 _ABSOLUTE = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 #: Words that say what this post takes for granted.
-_GRANTED = {"G21", "G40", "G43", "G49", "G90", "G94", "G54", "G55", "G56", "G57", "G58", "G59"}
-_OFFSETS = {"G54", "G55", "G56", "G57", "G58", "G59"}
+_GRANTED = {"G21", "G40", "G43", "G49", "G90", "G94"}
+#: Which work offset of the control a fixture selects.
+_OFFSETS = {**{f"G{53 + n}": n for n in range(1, 7)}, **{f"G59.{n}": 6 + n for n in range(1, 10)}}
 _COOLANTS = {"Flood": "FLOOD", "Mist": "MIST"}
 #: Lengths below this are none, mm.
 _POINT = 1e-6
@@ -67,8 +68,6 @@ def export(objects: Iterable[Any], filename: str, argstring: str) -> str:
     program = Path("freecad.nc" if filename == "-" else filename).resolve()
     _write(source := program.with_suffix(".apt"), text)
     given = [] if "--report" in arguments else ["--report", str(program.with_suffix(".html"))]
-    if len(writer.offsets) > 1:
-        given += ["--set", "work_offset=" + writer.offset_setting()]
     if len(writer.planes) > 1 and not any(each.startswith("frame=") for each in arguments):
         given += ["--set", "frame=absolute"]
     _post([str(source), "--output", str(program), *given, *arguments], writer.begins)
@@ -182,7 +181,7 @@ class Writer:
         self.offsets: list[str] = []
         self.planes: list[tuple[float, ...]] = [_ABSOLUTE]
         self._plane: tuple[float, ...] = _ABSOLUTE
-        self._used: dict[str, str] = {}
+        self._used: set[str] = set()
         self._controller: Any = None
         self._offset = ""
         self._at: list[float | None] = [None, None, None]
@@ -197,11 +196,6 @@ class Writer:
             raise RefusedError("the job has no active operation with motion")
         return "\n".join([*self.lines, "FINI"]) + "\n"
 
-    def offset_setting(self) -> str:
-        """Return the work offsets of the operations, as the setting ``work_offset`` takes them."""
-        others = [f"{name}:{offset}" for name, offset in self._used.items() if offset != self.offsets[0]]
-        return ",".join([self.offsets[0], *others])
-
     def _object(self, given: Any) -> None:
         if not all(getattr(each, "Active", True) for each in dressed(given)):
             return
@@ -209,7 +203,7 @@ class Writer:
             self._controller, self._at = given, [None, None, None]
             return
         commands = list(getattr(getattr(given, "Path", None), "Commands", ()))
-        offset = next((each.Name for each in commands if each.Name in _OFFSETS), "")
+        offset = next((name for name in (_code(each.Name) for each in commands) if name in _OFFSETS), "")
         if offset:
             self._offset, self._at = offset, [None, None, None]
             self.offsets += [offset] * (offset not in self.offsets)
@@ -226,7 +220,7 @@ class Writer:
         name = label if len(self.offsets) < 2 else f"{label} {self._offset}"
         others = (f"{label} {again}" for again in range(2, len(self._used) + 3))
         name = next(each for each in (name, *others) if each not in self._used)
-        self._used[name] = self._offset
+        self._used.add(name)
         plane = work_plane(given)
         if any(work_plane(each) != plane for each in chain):
             raise RefusedError(f"operation {label}: its work plane is not that of the operation that it changes")
@@ -237,6 +231,7 @@ class Writer:
             f"TOOL PATH/{name},TOOL,{_line(controller.Label)}",
             tool_statement(getattr(controller, "Tool", None)),
             "MSYS/" + ",".join(_text(value, 9) for value in plane),
+            *(f"$$-> WORK-OFFSET / {n}" for fixture, n in _OFFSETS.items() if fixture == self._offset),
             f"LOADTL/{controller.ToolNumber}",
         ]
         speed = _number(controller.SpindleSpeed)
@@ -321,7 +316,7 @@ class _Path:
             self.lines.append("SPINDL/RPM,{},{}".format(_text(words["S"]), "CLW" if name == "M3" else "CCLW"))
         elif name == "M6" and words.get("T", self._tool) != self._tool:
             raise self._refused(f"M6 T{words['T']:g} loads another tool than that of the operation")
-        elif name != "M6" and name not in _GRANTED:
+        elif name != "M6" and name not in _GRANTED and name not in _OFFSETS:
             raise self._refused(f"{command.Name} is not known")
 
     def _refused(self, why: str) -> RefusedError:

@@ -163,8 +163,7 @@ class Coolant(Event):
 class CutterComp(Event):
     """Cutter radius compensation: ``side`` is LEFT, RIGHT, ON or OFF.
 
-    plane     XYPLAN, ZXPLAN, YZPLAN or empty
-    register  0 if none is given
+    plane, register  XYPLAN, ZXPLAN, YZPLAN or empty; 0 if none is given
     contour   the points behind it are those of the contour, and the control adds the radius; else of the tool's centre
     """
 
@@ -216,8 +215,7 @@ class ShopStatement(Event):
     """A statement of which the definition of the machine has a template.
 
     text     as it stands in the CL file, without its word
-    word     its word
-    words    its values that are words
+    word, words  its word; its values that are words
     numbers  its values that are numbers
     """
 
@@ -345,7 +343,8 @@ class Frame:
 class Operation:
     """One tool path: its tool, coordinate system, moves and events; ``line`` is that of its TOOL PATH in ``file``.
 
-    ``splines`` are those for which rows of ``moves`` stand; ``joined`` names operations that it goes on with.
+    ``splines`` are those for which rows of ``moves`` stand; ``joined`` names operations that it goes on with;
+    ``work_offset`` counts those of the control from 1, 0: not stated.
     """
 
     name: str
@@ -360,6 +359,7 @@ class Operation:
     file: str = ""
     splines: Splines = field(default_factory=Splines.empty)
     joined: tuple[str, ...] = ()
+    work_offset: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

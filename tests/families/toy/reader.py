@@ -109,7 +109,14 @@ class ToyInterpreter(Rs274Interpreter[ActiveProgram]):
 READER: Final = FamilyReader(
     ToyInterpreter,
     frozenset(),
-    WorkOffsetWords("1 to 99", re.compile(r"([0-9]{1,2})"), first_number, lambda value: f"ORIGIN {value}", plain=True),
+    WorkOffsetWords(
+        "1 to 99",
+        re.compile(r"([0-9]{1,2})"),
+        first_number,
+        lambda value: f"ORIGIN {value}",
+        lambda n: n if n <= 99 else 0,
+        plain=True,
+    ),
     is_own_word=lambda word: False,
     comments=rb";[^\n]*",
     uses_length_numbers=False,

@@ -210,7 +210,7 @@ def inches() -> Stream:
 
 def set_ups() -> Stream:
     """Two set-ups, each with its work offset."""
-    job = Stream("TWO SIDES", says_offsets=True, properties={"workOffsets": "stated"})
+    job = Stream("TWO SIDES", has_offsets=True)
     other = {"origin": (0.0, 0.0, -50.0), "x": (1.0, 0.0, 0.0), "y": (0.0, -1.0, 0.0)}
     with job.section("FIRST SIDE", MILL, (30.0, 30.0, 50.0), offset=1):
         square(job, 25.0, 1.0)

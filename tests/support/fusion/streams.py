@@ -99,7 +99,7 @@ class Stream:
     inserts: dict[str, str] = field(default_factory=dict)
     properties: dict[str, str] = field(default_factory=dict)
     stock: tuple[Vector, Vector] | None = ((-60.0, -60.0, -50.0), (60.0, 60.0, 0.0))
-    says_offsets: bool = False
+    has_offsets: bool = False
     sections: list[dict[str, Any]] = field(default_factory=list)
     comment: str = ""
     lines: list[str] = field(default_factory=list)
@@ -114,7 +114,7 @@ class Stream:
     def text(self) -> str:
         """The CL file."""
         head = ["$$-> TRUNNION / 1", f"PARTNO/{self.name}", f"UNITS/{'INCHES' if self.inch else 'MM'}"]
-        if self.stock and not self.says_offsets:
+        if self.stock and not self.has_offsets:
             low, high = self.stock
             size = [b - a for a, b in zip(low, high, strict=True)]
             head.append(f"$$-> STOCK / BOX,{listed(*size, *low)}")
@@ -138,7 +138,7 @@ class Stream:
         parameters: dict[str, Any] = {"operation-comment": name, "operation:tolerance": 0.0005 if self.inch else 0.01}
         parameters.update(more.pop("parameters", {}))
         spindle = more.pop("spindle", 4000.0)
-        offset = more.get("offset", 1)
+        offset = more.get("offset", 1) or 1  # 0: the first
         self._now = {
             "tool": tool.event(), "plane": plane, "axis": axis, "fiveAxis": axis is not None, "start": start,
             "spindle": spindle, "offset": 1, "wcs": {"origin": NOWHERE, "x": LEVEL[0], "y": LEVEL[1]},
@@ -152,7 +152,7 @@ class Stream:
             f"TOOL PATH/{name},TOOL,{tool.name}", *tool.lines(),
             f"MSYS/{listed(*NOWHERE)},{listed(*plane[0], *plane[1], decimals=9)}",
             f"INTOL/{tolerance}", f"OUTTOL/{tolerance}",
-            *([f"$$ WORK OFFSET {offset}", f"PPRINT/WORK OFFSET {offset}"] if self.says_offsets else []),
+            f"$$-> WORK-OFFSET / {offset}",
             *self._said,
             *([f"STOP/T{tool.number}"] if dict(tool.others).get("manualToolChange") else []),
             f"LOADTL/{tool.number},ADJUST,{tool.number}",

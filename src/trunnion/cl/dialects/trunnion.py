@@ -13,7 +13,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import Dialect
 from trunnion.cl.dialects.clsf import CLSF
 from trunnion.cl.state import ReaderState
-from trunnion.cl.statement import Statement, joined_lines, numbers
+from trunnion.cl.statement import Statement, joined_lines, numbers, whole_number
 from trunnion.cl.statements import HANDLERS, apt_tools, operations
 from trunnion.cl.text_format import APT_TEXT
 from trunnion.messages import Wording, phrase
@@ -127,6 +127,27 @@ def _holder(state: ReaderState, statement: Statement) -> None:
     state.builder.tool = replace(tool, holder=name)
 
 
+def _work_offset(state: ReaderState, statement: Statement) -> None:
+    """Set which work offset of the control the operation is made in, before its motion."""
+    _stay_in_operation(state, statement)
+    if state.operation_row:
+        raise StatementError(Wording("CL350", "profile_behind_motion", major=statement.major.removeprefix("->")))
+    number = whole_number("WORK-OFFSET", statement.values)
+    if number < 1:
+        raise StatementError(Wording("CL330", "profile_work_offset", listed=statement.listed()))
+    state.state_once("work offset", number)
+    state.builder.work_offset = number
+
+
+def _end_of_file(state: ReaderState, statement: Statement) -> None:
+    """End the file: where an operation states its work offset, those that move do, too."""
+    if any(builder.work_offset for builder in state.builders):
+        for builder in state.builders:
+            if not builder.work_offset and builder.stop > builder.first:
+                state.diagnostics.error(builder.line, Wording("CL490", "not_stated", operation=builder.name))
+    operations.end_of_file(state, statement)
+
+
 def _probe(state: ReaderState, statement: Statement) -> None:
     """Keep a probing cycle: what becomes of it only the definition of a machine can say."""
     _stay_in_operation(state, statement)
@@ -159,7 +180,9 @@ def _comment(state: ReaderState, text: str) -> None:
         raise StatementError(Wording("CL160", "blank_before_arrow", text=text.strip()[:40]))
 
 
-_COMMANDS: Final = {"->TRUNNION": _version, "->STOCK": _stock, "->TOOL": _tool, "->HOLDER": _holder}
+_COMMANDS: Final = {
+    "->TRUNNION": _version, "->STOCK": _stock, "->TOOL": _tool, "->HOLDER": _holder, "->WORK-OFFSET": _work_offset,
+}  # fmt: skip
 
 TRUNNION: Final = Dialect(
     name="trunnion",
@@ -174,6 +197,7 @@ TRUNNION: Final = Dialect(
         "SELCTL": apt_tools.select,
         "PAINT": _paint,
         "PROBE": _probe,
+        "FINI": _end_of_file,
     },
     cycles=CycleWords(CLSF.cycles.modes),
     text=APT_TEXT,

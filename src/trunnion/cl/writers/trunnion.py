@@ -28,6 +28,7 @@ class TrunnionWriter(ClsfWriter):
     name = "trunnion"
     title = "Trunnion APT"
     has_stock = True
+    has_work_offsets = True
 
     def prepared(self, toolpath: Toolpath) -> Toolpath:
         """Return the toolpath as it is; a coordinate system whose meaning is not settled is lost."""
@@ -66,6 +67,11 @@ class TrunnionWriter(ClsfWriter):
             numbers = ",".join(number_text(float(size) / unit, 4) for size in sizes.split(","))
             lines.append(f"$$-> STOCK / {kind.upper()},{numbers}")
         return lines
+
+    def begin(self, number: int, operation: Operation) -> list[str]:
+        """Return what sections of NX begin with, and the work offset."""
+        offset = [f"$$-> WORK-OFFSET / {operation.work_offset}"] if operation.work_offset else []
+        return [*super().begin(number, operation), *offset]
 
     def foot(self) -> list[str]:
         """Return the end of the file."""

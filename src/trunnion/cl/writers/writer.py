@@ -10,7 +10,7 @@ import codecs
 from abc import ABC, abstractmethod
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from typing import BinaryIO, ClassVar
 
 import numpy as np
@@ -76,6 +76,7 @@ class ClWriter(ABC):
     comma     between two values
     form      of a point
     has_stock  a file says what the stock is
+    has_work_offsets  an operation says in which work offset it is
     """
 
     name: ClassVar[str]
@@ -85,12 +86,17 @@ class ClWriter(ABC):
     form: ClassVar[PointForm] = PointForm()
     divides_lines: ClassVar[bool] = True
     has_stock: ClassVar[bool] = False
+    has_work_offsets: ClassVar[bool] = False
 
     def __init__(self, toolpath: Toolpath, *, inch: bool = False) -> None:
         self.remarks: list[Problem] = []
         self.source = toolpath
         if toolpath.stock and not self.has_stock:
             self.remark(0, Wording("CL930", "stock", title=self.title))
+        if not self.has_work_offsets and any(operation.work_offset for operation in toolpath.operations):
+            self.remark(0, Wording("CL930", "work_offsets", title=self.title))
+            without = tuple(replace(operation, work_offset=0) for operation in toolpath.operations)
+            toolpath = replace(toolpath, operations=without)
         self.toolpath = self.prepared(toolpath)
         self.inch = inch
 

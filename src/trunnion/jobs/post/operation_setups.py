@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Final
 
 from trunnion import readers
+from trunnion.jobs.inputs.stated_offsets import with_stated_offsets
 from trunnion.jobs.inputs.tool_lengths import called_tools, with_lengths_of_tools
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.machines import Machine
@@ -24,8 +25,9 @@ _DELTA: Final = "delta_length"
 
 
 def with_operation_setups(toolpaths: Sequence[Toolpath], job: PostJob) -> PostJob:
-    """Return the job with the machine of each operation; itself where all have the same."""
-    tools = None
+    """Return the job with the work offset that each operation states, and its machine; none where all have the same."""
+    _, own_settings = with_stated_offsets(toolpaths, (job.machine, job.control), job.settings, job.own_settings)
+    job, tools = replace(job, own_settings=own_settings), None
     if job.simulation is not None:
         from trunnion.jobs.inputs.bodies import known_tools
 

@@ -15,6 +15,7 @@ from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths, cl_reading
 from trunnion.jobs.inputs.settings import Settings, check_operation_names, number_setting
+from trunnion.jobs.inputs.stated_offsets import with_stated_offsets
 from trunnion.jobs.inputs.stated_operations import with_stated_operations
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.forced_program import forced_notices
@@ -124,6 +125,7 @@ def load_toolpaths(
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
     toolpaths = replace_unknown_statements(changed(_with_repeated(toolpaths)), job.control, job.machine)
     toolpaths = with_stated_operations(toolpaths, job.settings)
+    toolpaths, _ = with_stated_offsets(toolpaths, (job.machine, job.control), job.settings, job.own_settings)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths
@@ -206,7 +208,9 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
         if len(operation.moves)
     ]
     check_operation_names(job.own_settings, job.settings, [name for _, name in cut])
-    observer.problems(_settings_of_twins(job.own_settings, cut))
+    stated = {operation.name for each in toolpaths for operation in each.operations if operation.work_offset}
+    given = {name: own for name, own in job.own_settings.items() if name not in stated or set(own) != {"work_offset"}}
+    observer.problems(_settings_of_twins(given, cut))
     planned = _planned(toolpaths, job)
     planned = replace(planned, decisions=(*job.decisions, *planned.decisions))
     observer.planned(planned)

@@ -13,6 +13,7 @@ from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.control_settings import default_settings
 from trunnion.jobs.inputs.settings import as_texts, check_operation_names, check_settings, split_by_operation
+from trunnion.jobs.inputs.stated_offsets import with_stated_offsets
 from trunnion.jobs.verify.arguments import DEFAULT_TOLERANCE
 from trunnion.jobs.verify.expected_values import expected_values
 from trunnion.jobs.verify.reading import ReadProgram, VerifiedMachine
@@ -49,7 +50,9 @@ def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> 
     single = {name: {**own_repeated.get(name, {})} for name in (*own_repeated, *of_operations)}
     for name, value in of_operations.items():
         single[name]["work_offset"] = value
-    by_operation = {name: {**settings, **values} for name, values in single.items()}
+    every = {**repeated, **({"work_offset": offset} if offset else {})}
+    _, own_settings = with_stated_offsets(read.toolpaths, (on.machine, on.control), every, single)
+    by_operation = {name: {**settings, **values} for name, values in own_settings.items()}
     return replace(
         expected_values(on.control, on.machine, settings, by_operation),
         span=given["span"],

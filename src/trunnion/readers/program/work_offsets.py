@@ -15,6 +15,7 @@ class WorkOffsetWords:
     words  regular expression of one of them, with a group for each number
     value  ``Run.work_offset`` of the numbers of its groups (None where a group is absent); 0 for none
     name   the word that selects a value, as messages call it
+    nth    the value of the first, the second and so on, from 1; 0 where the control has not so many
     plain  the setting ``work_offset`` is the number alone
     """
 
@@ -22,6 +23,7 @@ class WorkOffsetWords:
     words: re.Pattern[str]
     value: Callable[[tuple[int | None, ...]], int]
     name: Callable[[int], str]
+    nth: Callable[[int], int]
     plain: bool = False
 
     @property

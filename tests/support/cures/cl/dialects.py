@@ -229,5 +229,11 @@ CURES: Final = (
          "- $$-> STOCK / CYLINDER,9,9,0"),
     _own("CL350 profile_outside", *_NAMED, "- $$-> HOLDER / HSK 63", "TOOL PATH/A,TOOL,B", "+ $$-> HOLDER / HSK 63",
          *_FINISH[1:]),
+    _own("CL330 profile_work_offset", *_NAMED, *_FINISH[:2], "- $$-> WORK-OFFSET / 0", "+ $$-> WORK-OFFSET / 2",
+         *_FINISH[2:]),
+    _own("CL350 profile_behind_motion", *_NAMED, *_FINISH[:2], "+ $$-> WORK-OFFSET / 2", *_FINISH[2:],
+         "- $$-> WORK-OFFSET / 2"),
+    _own("CL490 not_stated", *_NAMED, *_FINISH[:2], "+ $$-> WORK-OFFSET / 1", *_FINISH[2:], "END-OF-PATH",
+         "TOOL PATH/C,TOOL,B", "$$-> WORK-OFFSET / 2", *_FINISH[1:]),
     _own("CL410 profile_units", *_NAMED[:1], "+ UNITS/MM", *_FINISH),
 )  # fmt: skip

@@ -112,6 +112,8 @@ CURES: Final = (
            "LOADTL/5", "GOTO/0,0,9", "FINI"),
     marked("CL930 stock", _written("clsf"), "$$-> TRUNNION / 1", "UNITS/MM", "$$-> STOCK / CYLINDER,9,9,0",
            "TOOL PATH/A,TOOL,B", "FEDRAT/MMPM,100", "GOTO/0,0,5", "END-OF-PATH", "FINI"),
+    marked("CL930 work_offsets", _written("clsf"), "$$-> TRUNNION / 1", "UNITS/MM", "TOOL PATH/A,TOOL,B",
+           "$$-> WORK-OFFSET / 2", "FEDRAT/MMPM,100", "GOTO/0,0,5", "END-OF-PATH", "FINI"),
     _other("CL920 would_read_back_another", "6.5000000000", "5.5000000000", _MATRIX),
     marked("CL930 unsettled_system", _written("catia"), _CSYS.rstrip()),
     _to("catia", "CL930 not_carried_over",

@@ -11,6 +11,9 @@ from trunnion.readers.program.work_offsets import WorkOffsetWords, g_word
 #: The value of G54.1 P1 less 1.
 _EXTENDED_BASE: Final = 600
 
+#: How many there are before the extended ones: G54 to G59.
+_PLAIN: Final = 6
+
 
 def extended_offset(number: int, highest: int = HIGHEST_EXTENDED) -> int:
     """Return the value of the column ``work_offset`` for P of G54.1; 0 if there is none of this number."""
@@ -29,6 +32,7 @@ def _offsets(word: str, highest: int) -> WorkOffsetWords:
         re.compile(rf"G(5[4-9])|{re.escape(word)} ?P([0-9]{{1,3}})"),
         lambda numbers: numbers[0] or extended_offset(numbers[1] or 0, highest),
         partial(offset_name, extended=word),
+        lambda n: 53 + n if n <= _PLAIN else extended_offset(n - _PLAIN, highest),
     )
 
 

@@ -16,6 +16,7 @@ WORK_OFFSETS: Final = WorkOffsetWords(
     re.compile(r"G55 O([0-9]{1,2})"),
     lambda numbers: OFFSET_BASE + numbers[0] if numbers[0] else 0,
     lambda value: f"G55 O{value - OFFSET_BASE}",
+    lambda n: OFFSET_BASE + n if n <= 99 else 0,
 )
 
 RAW_WORDS: Final = raw_words(

@@ -29,6 +29,7 @@ WORK_OFFSETS: Final = WorkOffsetWords(
     re.compile(r"(?:PRESET )?([0-9]{1,4})"),
     first_number,
     lambda value: f"preset {value}",
+    lambda n: n if n <= 9999 else 0,
     plain=True,
 )
 

@@ -17,6 +17,7 @@ WORK_OFFSETS: Final = WorkOffsetWords(
     re.compile(r"G(5[4-9])|G59\.([1-3])"),
     lambda numbers: numbers[0] or 590 + (numbers[1] or 0),
     lambda value: f"G{value / 10:g}" if value > 590 else g_word(value),
+    lambda n: 53 + n if n <= 6 else 584 + n if n <= 9 else 0,
 )
 
 #: Parameters up to 5000 and named ones are the program's. M48 to M53 switch overrides.

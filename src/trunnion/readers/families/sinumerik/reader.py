@@ -21,7 +21,11 @@ from trunnion.readers.program.work_offsets import WorkOffsetWords, first_number,
 
 #: G54 to G57 and G505 to G599.
 WORK_OFFSETS: Final = WorkOffsetWords(
-    "G54 to G57, or G505 to G599", re.compile(r"G(5[4-7]|5(?:0[5-9]|[1-9][0-9]))"), first_number, g_word
+    "G54 to G57, or G505 to G599",
+    re.compile(r"G(5[4-7]|5(?:0[5-9]|[1-9][0-9]))"),
+    first_number,
+    g_word,
+    lambda n: 53 + n if n <= 4 else 500 + n if n <= 99 else 0,
 )
 
 _VALUE: Final = rf"(?:{NUMBER}|[-+]?R[0-9]+)"
