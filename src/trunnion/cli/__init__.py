@@ -9,6 +9,7 @@ import logging
 import os
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from importlib import import_module
 from typing import TYPE_CHECKING, NoReturn
 
@@ -147,9 +148,14 @@ def _carry_out(given: "Given") -> int:
         check_replaced(given)
     module, _, name = given.job.run.partition(":")
     run: Callable[[Given], int] = getattr(import_module(module), name)
-    if not given.typed:
-        return run(given)
-    from trunnion.jobs.inputs.settings import reported_as_arguments
+    with ExitStack() as around:
+        if given.typed:
+            from trunnion.jobs.inputs.settings import reported_as_arguments
 
-    with reported_as_arguments({setting: option.name for setting, option in given.typed.items()}):
+            typed = {setting: option.name for setting, option in given.typed.items()}
+            around.enter_context(reported_as_arguments(typed))
+        if not given.job.goes_on:
+            from trunnion.files import command_output
+
+            around.enter_context(command_output())
         return run(given)

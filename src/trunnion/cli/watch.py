@@ -16,7 +16,7 @@ from trunnion.cli.project import outputs_of
 from trunnion.cli.terminal import warn_of_old
 from trunnion.cli.wording import problem_lines, said
 from trunnion.errors import Problem, RefusedError, TrunnionError
-from trunnion.files import OutputGroup, file_on_disk, output_group
+from trunnion.files import OutputGroup, file_on_disk, output_at_once, output_group
 from trunnion.jobs.inputs.bodies import fixture_files
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import load_machine
@@ -94,7 +94,7 @@ class _Told:
     def work(self, is_unchanged: Callable[[], bool]) -> None:
         """Post once, and say what became of it."""
         try:
-            with output_group() as group:
+            with output_at_once(), output_group() as group:
                 may_run, written = self._work.post(group)
                 if not is_unchanged():
                     raise _ChangedError

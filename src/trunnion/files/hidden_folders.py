@@ -26,9 +26,13 @@ JOURNAL: Final = ".trunnion-journal"
 
 
 class HiddenFolders:
-    """Folders that are removed with everything in them, whatever happens."""
+    """Folders that are removed with everything in them, whatever happens.
+
+    is_waiting  whether complete files wait in them for others, so that they stay when their own job ends
+    """
 
     def __init__(self) -> None:
+        self.is_waiting = False
         self._folders: dict[Path, Path] = {}
         self._locks: list[FolderLock] = []
 
@@ -66,6 +70,8 @@ class HiddenFolders:
         One with a journal stays: its files could not be brought to their places, nor back, and the next command tries
         it again.
         """
+        if self.is_waiting:
+            return
         with held_interrupts():
             self._remove_contents()  # before the locks go: nobody takes them for those of a dead job
             for lock in self._locks:

@@ -6,17 +6,19 @@ import os
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
 from trunnion.errors import InputError, Problem
+from trunnion.files.command_output import move_together, once_in_place
 from trunnion.files.dead_jobs import remove_temporary_folders, settle_and_log
 from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.edited import place_of_edited
 from trunnion.files.hidden_folders import HiddenFolders
 from trunnion.files.interrupts import held_interrupts
 from trunnion.files.journal import Record
-from trunnion.files.moves import Moves, moving_alone
+from trunnion.files.moves import Moves
 from trunnion.files.places import Claims, OutputPlace, cannot_write, resolve_output
 from trunnion.files.streams import open_stream, send, stream_name
 from trunnion.messages import Wording
@@ -212,19 +214,13 @@ class OutputFiles:
 
     def publish(self, hidden: HiddenFolders, stream: BinaryIO | None) -> None:
         """Bring all files to their places, once they are closed; the first one goes to the stream if there is one."""
-        with moving_alone(self.places):
-            self._publish(hidden, stream)
-
-    def _publish(self, hidden: HiddenFolders, stream: BinaryIO | None) -> None:
-        moves = Moves()
-        self.bring(hidden, moves, main=stream is None)
         if stream is not None:
             _send(self.path, stream, self._place.name if self._place else stream_name(stream))
         for path, place in self.papers:
             if place.is_stream:
                 with open_stream(place) as device:
                     _send(path, device, place.name)
-        moves.carry_out()
+        move_together(partial(self.bring, hidden, main=stream is None), self.places, [hidden])
 
     def bring(self, hidden: HiddenFolders, moves: Moves, *, main: bool = True) -> None:
         """Add the complete files to those that move to their places; ``main``: the first one is among them.
@@ -246,7 +242,7 @@ class OutputFiles:
         """Record a paper that was written although the program is not."""
         place = resolve_output(paper)
         if self._earlier is not None and not place.is_stream:
-            self._earlier.remember([], [place.path])
+            once_in_place(partial(self._earlier.remember, [], [place.path]))
 
     def left_over(self, papers: Iterable[OutputPlace]) -> list[Path]:
         """Files that earlier jobs of the first file wrote with another program, and that stay beside this one.

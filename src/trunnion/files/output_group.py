@@ -6,11 +6,12 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem
+from trunnion.files.command_output import move_together
 from trunnion.files.dead_jobs import settle_and_log
 from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.hidden_folders import HiddenFolders
 from trunnion.files.journal import Names, Record
-from trunnion.files.moves import Moves, moving_alone
+from trunnion.files.moves import Moves
 from trunnion.files.output import OutputFiles
 from trunnion.files.places import Claims, OutputPlace
 from trunnion.messages import Wording
@@ -59,18 +60,17 @@ class OutputGroup:
 
     def publish(self) -> None:
         """Bring the files of all jobs to their places."""
-        with moving_alone(place for files, _ in self._complete for place in files.places):
-            self._publish()
+        places = [place for files, _ in self._complete for place in files.places]
+        move_together(self._bring, places, self._folders)
 
-    def _publish(self) -> None:
-        moves = Moves(names=self._names)
+    def _bring(self, moves: Moves) -> None:
+        moves.names += self._names
         for files, hidden in self._complete:
             files.bring(hidden, moves)
         for path, owner in self._owners.items():
             number = moves.number(path)
             assert number is not None, "the program of a job of the group"
             moves.records.append(Record(number, owner=owner))
-        moves.carry_out()
 
     def record_owner(self, program: Path, owner: Iterable[str]) -> None:
         """Record for whom a program of the group is written (``EarlierJob.set_owner``), once it is in its place."""

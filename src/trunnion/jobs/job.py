@@ -26,6 +26,7 @@ class Job:
     run       ``module:function`` of the command line, which takes what is given, and returns the exit code
     examples  what is typed, and what it does
     guards    whether it finds out itself which files it must not write over: it begins to work before that is known
+    goes_on   whether it goes on after it has written files, which then appear one by one and not when it ends
     """
 
     name: str
@@ -34,6 +35,7 @@ class Job:
     run: str
     examples: tuple[tuple[str, str], ...] = ()
     guards: bool = False
+    goes_on: bool = False
 
     @property
     def arguments(self) -> list[Option]:
@@ -56,10 +58,11 @@ class Job:
 
 
 def job(
-    name: str, title: str, *options: Option | Group, run: str, examples: Iterable[tuple[str, str]], guards: bool = False
-) -> Job:
+    name: str, title: str, *options: Option | Group, run: str, examples: Iterable[tuple[str, str]],
+    guards: bool = False, goes_on: bool = False,
+) -> Job:  # fmt: skip
     """Declare a command."""
-    return Job(name, title, flat(options), f"trunnion.cli.{run}", tuple(examples), guards)
+    return Job(name, title, flat(options), f"trunnion.cli.{run}", tuple(examples), guards, goes_on)
 
 
 class Given:

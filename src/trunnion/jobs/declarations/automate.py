@@ -65,6 +65,7 @@ _BATCH: Final = job(
     ),
     Option("report", "--report", Choice(("html", "json")), "a report of each file", heading=_FOLDER),
     run="many_files.batch:run",
+    goes_on=True,
     examples=[
         ("trunnion batch jobs.toml", "what the file states, and only what is not done yet"),
         ("trunnion batch cl --action post --machine yl569 --results nc", "every CL file of a folder"),
@@ -87,6 +88,7 @@ _SURVEY: Final = job(
     ),
     JSON,
     run="many_files.survey:run",
+    goes_on=True,
     examples=[
         ("trunnion survey cl_files", "what becomes of the files of a folder, on a machine of each control"),
         ("trunnion survey server --machine our_mill.toml --report survey.html", "on your machine, as a page"),
@@ -102,6 +104,7 @@ _TEST: Final = job(
     Option("accept", "--accept", Switch(), "show what differs, and take the new programs over"),
     JSON,
     run="cases:run",
+    goes_on=True,
     guards=True,
     examples=[
         ("trunnion test parts", "are all programs as they were?"),

@@ -96,6 +96,7 @@ _BUILD: Final = job(
     Option("file", "", FileIn("MACHINE.toml"), "definition; none: a new one", many=Many.MAYBE),
     SERVING,
     run="build:run",
+    goes_on=True,
     examples=[
         ("trunnion build", "a new machine"),
         ("trunnion build our_mill.toml", "go on with one"),

@@ -84,6 +84,7 @@ _VIEW: Final = job(
     LIVE.under(_CONNECTING),
     SERVING,
     run="view:run",
+    goes_on=True,
     examples=[
         ("trunnion view part.mpf --machine yl569", "block by block, in a browser"),
         ("trunnion view part.toml --output part.html", "a project, as one page that works offline"),
@@ -143,6 +144,7 @@ _TWIN: Final = job(
         "of the user who is added: operates the twin, or only looks", default="operator", own=True,
     ),
     run="twin:run",
+    goes_on=True,
     examples=[
         ("trunnion twin part.mpf --machine yl569 --loop", "a machine that runs it again and again"),
         ("trunnion twin --add-user anna", "a user for other computers"),
@@ -159,6 +161,7 @@ _RECORD: Final = job(
     Option("seconds", "--seconds", seconds(1e9, "N"), "how long; without it until Ctrl-C"),
     LIVE,
     run="record:run",
+    goes_on=True,
     examples=[
         ("trunnion record opc.tcp://localhost:4840 --output run.csv", "until Ctrl-C"),
         ("trunnion verify part.mpf --machine yl569 --recorded run.csv", "then compare it with the program"),

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from trunnion.controls.definition import SubprogramNaming
 from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.files import EarlierJob, OutputFiles, resolve_output
+from trunnion.files import EarlierJob, OutputFiles, once_in_place, resolve_output
 from trunnion.files.places import cannot_write
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.machining import operation_names
@@ -65,6 +65,9 @@ class ImpellerFiles:
 
     def remember_report(self) -> None:
         """Record that the report, if there is one, is this cut's."""
+        once_in_place(self._remember_report)
+
+    def _remember_report(self) -> None:
         place = resolve_output(self.report)
         if place.path.exists():
             EarlierJob(place.path).remember([place.path])
